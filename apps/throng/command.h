@@ -55,6 +55,9 @@ int fail(const Error& error);
 
 /// Prints "throng: note: <sentence>" on standard error.
 void note(const std::string& sentence);
+/// What the program says if a signal ends it from now on, at once and wherever it is; empty: the
+/// first signal asks it to stop. Of several ranks the first two speak.
+void last_words(const std::string& sentence);
 
 /// A subcommand with --json and an example that `--help` shows and that works as printed: one
 /// command per line, run in order in an empty folder by scripts/tests/test_examples.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 #include <new>
 #include <string>
@@ -34,11 +35,16 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A signal handler can reach nothing but a global; this is the program's only one.
+// A signal handler can reach nothing but globals; these are the program's only ones.
 std::atomic<std::atomic<bool>*> g_cancel = nullptr;
+std::atomic<const char*> g_last_words = nullptr;
 
 // The first Ctrl-C asks the work to stop and clean up; the second does not wait for it.
 extern "C" void on_interrupt(int) {
+  if (const char* const words = g_last_words.load(); words != nullptr) {
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, words, std::strlen(words));
+    _exit(kInterrupted);
+  }
   std::atomic<bool>* const cancel = g_cancel.load();
   if (cancel == nullptr || cancel->exchange(true)) _exit(kInterrupted);
 }
@@ -152,6 +158,18 @@ int run_program(int argc, const char* const* argv,
   progress_line().clear();
   g_cancel = nullptr;
   return session.exit_code;
+}
+
+void last_words(const std::string& sentence) {
+  static std::string kept[2];  // the one that a signal may just be writing, and the next
+  static int next = 0;
+  if (sentence.empty() || rank_info().rank > 1) {  // As fail() does.
+    g_last_words = sentence.empty() ? nullptr : "";
+    return;
+  }
+  kept[next] = "throng: " + sentence + "\n";
+  g_last_words = kept[next].c_str();
+  next = 1 - next;
 }
 
 void show_progress(Session& session, std::string_view stage, uint64_t done, uint64_t total) {

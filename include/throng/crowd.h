@@ -284,7 +284,8 @@ struct CrowdReport {
   // Of crowd_over_ranks.
   int32_t ranks = 1;          ///< That share the crowd.
   uint64_t most_avatars = 0;  ///< Avatars that one rank moves, at most.
-  uint64_t sent_bytes = 0;    ///< To neighbours in this step, by the rank that sent most. [bytes]
+  /// By the rank that sent most in this step: to each neighbour, and once to all. [bytes]
+  uint64_t sent_bytes = 0;
   /// Mean speed towards the next corner, divided by the desired speed, on stairs and slopes by what
   /// that is there. [-1 to 1]
   double progress = 0;
@@ -475,12 +476,20 @@ class THRONG_API Crowd {
 /// keeps only them. All that a crowd returns but memory() is as in one process, bit for bit, on all
 /// ranks and for any number of them; what reads states gathers those of all avatars, once between
 /// two steps. config.workers is per rank; 0 shares the cores of a machine among its
-/// ranks. Classes that fly or go over nodes, off-mesh links, and save() are for one process. Fails
+/// ranks. save() gathers the whole crowd on each rank. Classes that fly or go over nodes, and
+/// off-mesh links, are for one process. Fails
 /// as Crowd::create, with kBadConfig if the edits have off-mesh links, or if there are several
 /// ranks and the library was built without MPI. If a rank dies, mpirun ends the others.
 /// docs/design/019-ranks.md.
 [[nodiscard]] THRONG_API Result<Crowd> crowd_over_ranks(const World& world,
                                                         const CrowdConfig& config);
+/// Crowd::restore by all ranks, of what one process or any number of ranks have saved: every rank
+/// gives all of it. Memory: at first each rank has all avatars. Fails as Crowd::restore and
+/// crowd_over_ranks do.
+[[nodiscard]] THRONG_API Result<Crowd> restore_over_ranks(const World& world,
+                                                          const CrowdConfig& config,
+                                                          std::span<const uint8_t> saved,
+                                                          Context& context);
 
 // ----
 // Avatar generators: keep a crowd populated around a viewer's eye. Only what the eye sees, and a

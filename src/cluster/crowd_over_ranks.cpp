@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cluster/job_assignment.h"
@@ -15,7 +16,17 @@ namespace {
 
 class StartedTogether final : public RankGroup {
  public:
-  explicit StartedTogether(cluster::Ranks& ranks) : ranks_(ranks) {}
+  static Result<StartedTogether*> join() {
+    auto joined = cluster::Ranks::join();
+    if (!joined) return joined.error();
+    static StartedTogether group(**joined);
+    return &group;
+  }
+  /// A rank's settings.
+  [[nodiscard]] CrowdConfig own(CrowdConfig config) const {
+    config.workers = cluster::workers_of_rank(config.workers, ranks_);
+    return config;
+  }
   [[nodiscard]] int32_t rank() const override { return ranks_.rank(); }
   [[nodiscard]] int32_t size() const override { return ranks_.size(); }
   std::span<const Bytes> gather(std::span<const uint8_t> mine) override {
@@ -32,6 +43,8 @@ class StartedTogether final : public RankGroup {
   }
 
  private:
+  explicit StartedTogether(cluster::Ranks& ranks) : ranks_(ranks) {}
+
   cluster::Ranks& ranks_;
   std::vector<Bytes> came_;
 };
@@ -40,12 +53,19 @@ class StartedTogether final : public RankGroup {
 
 Result<Crowd> crowd_over_ranks(const World& world, const CrowdConfig& config) {
   if (rank_info().size <= 1) return Crowd::create(world, config);
-  auto joined = cluster::Ranks::join();
-  if (!joined) return joined.error();
-  static StartedTogether group(**joined);
-  CrowdConfig own = config;
-  own.workers = cluster::workers_of_rank(config.workers, **joined);
-  return crowd::create_shared_crowd(world, own, group);
+  auto group = StartedTogether::join();
+  if (!group) return group.error();
+  return crowd::share_crowd(Crowd::create(world, (*group)->own(config)), **group);
+}
+
+Result<Crowd> restore_over_ranks(const World& world, const CrowdConfig& config,
+                                 std::span<const uint8_t> saved, Context& context) {
+  if (rank_info().size <= 1) return Crowd::restore(world, config, saved, context);
+  auto group = StartedTogether::join();
+  if (!group) return group.error();
+  auto crowd = Crowd::restore(world, (*group)->own(config), saved, context);
+  if (auto ok = agree_over_ranks(crowd ? Result<void>() : crowd.error()); !ok) return ok.error();
+  return crowd::share_crowd(std::move(crowd), **group);
 }
 
 }  // namespace throng

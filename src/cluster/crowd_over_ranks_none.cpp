@@ -9,4 +9,9 @@ Result<Crowd> crowd_over_ranks(const World& world, const CrowdConfig& config) {
   return Crowd::create(world, config);
 }
 
+Result<Crowd> restore_over_ranks(const World& world, const CrowdConfig& config,
+                                 std::span<const uint8_t> saved, Context& context) {
+  return Crowd::restore(world, config, saved, context);
+}
+
 }  // namespace throng

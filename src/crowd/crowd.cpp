@@ -135,6 +135,7 @@ CrowdReport Crowd::step() {
   const auto start = Clock::now();
   State& s = *state_;
   s.everywhere.clear();
+  if (s.shared.share) s.shared.share->forget_sent_bytes();
   s.follow_edits();
   CrowdReport report;
   report.step = ++s.shared.step;

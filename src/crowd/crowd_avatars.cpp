@@ -71,11 +71,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     return Error{Errc::kNotFound, ok.error().message};
   }
   if (mode_of_class[c] != nullptr) return {};
-  if (shared.share && (shared.flies(c) || shared.climbs(c))) {
-    return bad_config("class " + shared.body_class(c).name +
-                      (shared.flies(c) ? " flies" : " goes over nodes") +
-                      "; ranks share only avatars that walk: take another class or one process");
-  }
+  if (shared.share && (shared.flies(c) || shared.climbs(c))) return share_refused(c);
   auto ground = crowd::CrowdGround::create(data, static_cast<int32_t>(shared.baked_class(c)),
                                            world::step_mm(shared.body_class(c)));
   if (!ground) return ground.error();

@@ -405,16 +405,53 @@ bool are_sound(std::span<const crowd::Body> bodies, const Head& head, const Stat
   return sound;
 }
 
+// What of a saved crowd is of avatars: rows by name.
+struct SavedAvatars {
+  std::vector<crowd::Body> bodies;
+  std::vector<crowd::Orientation> orientations;
+  std::vector<uint8_t> walk;
+  std::vector<crowd::OwnCurves::Saved> own_curves;
+};
+
+template <class State>
+SavedAvatars saved_avatars(const State& s) {
+  SavedAvatars saved;
+  if (!s.shared.share) {
+    const std::span<const crowd::Body> bodies = s.walk.bodies();
+    saved.bodies.assign(bodies.begin(), bodies.end());
+    saved.orientations = s.shared.orientations;
+    s.walk.save(saved.walk);
+    saved.own_curves = s.own_curves.saved();
+    return saved;
+  }
+  const size_t names = s.shared.names.names();
+  saved.orientations.resize(names);
+  crowd::SavedWalkers walkers(names);
+  crowd::OwnCurves own_curves;
+  for (const auto& moved : s.moved_everywhere()) {
+    const crowd::Body& body = moved.walker.ghost.body;
+    saved.bodies.push_back(body);
+    saved.orientations[body.slot] = moved.orientation;
+    walkers.add(moved.walker);
+    if (moved.has_curves != 0) own_curves.set(body.slot, moved.curves);
+  }
+  walkers.save(s.walk.engine().queues(), saved.walk);
+  saved.own_curves = own_curves.saved();
+  return saved;
+}
+
 }  // namespace
 
 std::vector<uint8_t> Crowd::save() const {
   const State& s = *state_;
+  const SavedAvatars avatars = saved_avatars(s);
+  crowd::RankShare* const share = s.shared.share.get();
   Head head = head_of(s.shared.world, s.shared.config);
   head.step = s.shared.step;
   head.flows_are_old = s.walk.flows_are_old() ? 1 : 0;
   head.sub_step = s.shared.sub_step;
   head.scattered = s.scattered;
-  head.bodies = s.walk.bodies().size();
+  head.bodies = avatars.bodies.size();
   head.slots = s.shared.names.names();
   head.free_slots = s.shared.names.free_names().size();
   std::vector<std::array<double, 2>> corners;
@@ -440,22 +477,23 @@ std::vector<uint8_t> Crowd::save() const {
   head.taking_tallest = s.link.taking().tallest;
   std::vector<crowd::DelayMap::Saved> delays;
   if (const crowd::DelayMap* map = s.walk.delays(); map != nullptr) {
-    delays = map->saved();
-    head.questions = map->saved_questions();
+    delays = map->saved(share);
+    head.questions = map->saved_questions(share);
   }
   head.slow_levels = delays.size();
-  head.aside = s.walk.standing_aside().size();
+  const std::vector<crowd::StandsAside> aside =
+      share != nullptr ? s.walk.standing_aside_everywhere() : s.walk.standing_aside();
+  head.aside = aside.size();
   const std::vector<uint8_t> densities = crowd::save_densities(s.shared.density_classes);
   head.density_bytes = densities.size();
-  const std::vector<crowd::OwnCurves::Saved> own_curves = s.own_curves.saved();
-  head.own_curves = static_cast<uint32_t>(own_curves.size());
+  head.own_curves = static_cast<uint32_t>(avatars.own_curves.size());
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
-  put_rows(out, s.walk.bodies().data(), head.bodies);
+  put_rows(out, avatars.bodies.data(), head.bodies);
   put_rows(out, s.shared.names.generations().data(), head.slots);
-  put_rows(out, s.shared.orientations.data(), head.slots);
-  s.walk.save(out);
+  put_rows(out, avatars.orientations.data(), head.slots);
+  put_rows(out, avatars.walk.data(), avatars.walk.size());
   put_rows(out, s.shared.names.free_names().data(), head.free_slots);
   put_rows(out, obstacles.data(), head.obstacles);
   put_rows(out, corners.data(), head.corners);
@@ -469,9 +507,9 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, edits.data(), edits.size());
   put_rows(out, calls.data(), calls.size());
   put_rows(out, delays.data(), delays.size());
-  put_rows(out, s.walk.standing_aside().data(), head.aside);
+  put_rows(out, aside.data(), head.aside);
   put_rows(out, densities.data(), densities.size());
-  put_rows(out, own_curves.data(), own_curves.size());
+  put_rows(out, avatars.own_curves.data(), avatars.own_curves.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;

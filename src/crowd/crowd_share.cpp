@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/access.h"
+#include "core/arrays/release.h"
 #include "crowd/crowd_state.h"
 #include "crowd/shared_crowd.h"
 #include "crowd/standing_map.h"
@@ -19,29 +22,17 @@ constexpr double kMaxImbalance = 1.1;   // largest share of the avatars by the m
 constexpr uint64_t kStepsBetween = 50;  // at least, before columns are assigned again
 constexpr size_t kMinAvatars = 100;     // a rank: fewer are not worth it
 
-// All that is known of an avatar.
-struct Moved {
-  crowd::MovedWalker walker;
-  crowd::Orientation orientation = {};
-  uint64_t inside = 0;
-  std::array<int32_t, 3> checked_at = kNeverChecked;
-  uint32_t has_curves = 0;
-  CurvilinearTuning curves = {};
-};
-static_assert(std::is_trivially_copyable_v<Moved>);
-
-template <class Ids>
-void gather_ids(crowd::RankShare& share, Ids& ids) {
-  ids = share.gather(std::span<const typename Ids::value_type>(ids));
+template <class Values>
+uint32_t size_of(const Values& values) {
+  return static_cast<uint32_t>(values.size());
 }
 
 }  // namespace
 
 namespace crowd {
 
-Result<Crowd> create_shared_crowd(const World& world, const CrowdConfig& config, RankGroup& group) {
-  auto crowd = Crowd::create(world, config);
-  if (!crowd) return crowd.error();
+Result<Crowd> share_crowd(Result<Crowd> crowd, RankGroup& group) {
+  if (!crowd) return crowd;
   if (auto ok = Access::state(*crowd)->share_with(group); !ok) return ok.error();
   return crowd;
 }
@@ -52,12 +43,39 @@ std::vector<AvatarState> own_avatars(const Crowd& crowd) {
 
 }  // namespace crowd
 
+// Of the avatars that it has, each rank keeps those on its columns.
 Result<void> Crowd::State::share_with(RankGroup& group) {
+  for (const crowd::Body& body : walk.bodies()) {
+    if (&mode_of(body) != &link) return share_refused(body.avatar_class);
+  }
   const world::WorldData& data = *data_of(shared.world);
   shared.share = std::make_unique<crowd::RankShare>(group, data.width, data.depth);
+  if (auto ok = check_links(); !ok) return ok;
+  shared.share->assign_columns(walk.bodies());
+  assigned_for = walk.bodies().size();
+  assigned_at = shared.step;
+  std::vector<Moved> own;
+  for (size_t n = 0; n < walk.bodies().size(); ++n) {
+    if (shared.share->is_own(walk.bodies()[n])) own.push_back(moved(n, shared.sub_step));
+  }
   shared.names.share();
   walk.share();
-  return check_links();
+  if (crowd::DelayMap* delays = walk.delays(); delays != nullptr && group.rank() > 0) {
+    delays->forget_sums();
+  }
+  release(shared.orientations);
+  release(where);
+  own_curves = {};
+  for (const Moved& one : own) take(one, shared.sub_step);
+  where_is_old = true;
+  return {};
+}
+
+Error Crowd::State::share_refused(size_t avatar_class) const {
+  return {Errc::kBadConfig,
+          "crowd: class " + shared.body_class(avatar_class).name +
+              (shared.flies(avatar_class) ? " flies" : " goes over nodes") +
+              "; ranks share only avatars that walk: take another class or one process"};
 }
 
 Result<void> Crowd::State::check_links() const {
@@ -84,6 +102,43 @@ crowd::Body* Crowd::State::commanded(AvatarId id) {
   return here;
 }
 
+Crowd::State::Moved Crowd::State::moved(size_t n, uint64_t next) const {
+  const uint32_t slot = walk.bodies()[n].slot;
+  Moved moved{.walker = walk.moved(n, next),
+              .orientation = shared.orientations[slot],
+              .inside = slot < inside.size() ? inside[slot] : 0,
+              .checked_at = slot < checked_at.size() ? checked_at[slot] : kNeverChecked};
+  if (const CurvilinearTuning* curves = own_curves.find(slot); curves != nullptr) {
+    moved.has_curves = 1;
+    moved.curves = *curves;
+  }
+  return moved;
+}
+
+void Crowd::State::take(const Moved& moved, uint64_t next) {
+  const uint32_t slot = shared.names.take_slot(moved.walker.ghost.body.slot);
+  shared.orientations.resize(shared.names.slots());
+  where.resize(shared.names.slots(), kNoBody);
+  walk.take_over(moved.walker, slot, next);
+  shared.orientations[slot] = moved.orientation;
+  inside.resize(std::max(inside.size(), slot + size_t{1}), 0);
+  inside[slot] = moved.inside;
+  checked_at.resize(std::max(checked_at.size(), slot + size_t{1}), kNeverChecked);
+  checked_at[slot] = moved.checked_at;
+  if (moved.has_curves != 0) own_curves.set(slot, moved.curves);
+  shared.some_leave = shared.some_leave || moved.walker.ghost.body.leaves;
+}
+
+std::vector<Crowd::State::Moved> Crowd::State::moved_everywhere() const {
+  std::vector<Moved> own;
+  for (size_t n = 0; n < walk.bodies().size(); ++n) own.push_back(moved(n, shared.sub_step));
+  std::vector<Moved> all = shared.share->gather(std::span<const Moved>(own));
+  std::sort(all.begin(), all.end(), [](const Moved& a, const Moved& b) {
+    return a.walker.ghost.body.slot < b.walker.ghost.body.slot;
+  });
+  return all;
+}
+
 void Crowd::State::migrate() {
   crowd::RankShare& share = *shared.share;
   share.set_reach(walk.engine().sight());
@@ -104,23 +159,14 @@ void Crowd::State::migrate() {
       ++n;
       continue;
     }
-    Moved moved{
-        .walker = walk.moved(n),
-        .orientation = shared.orientations[body.slot],
-        .inside = body.slot < inside.size() ? inside[body.slot] : 0,
-        .checked_at = body.slot < checked_at.size() ? checked_at[body.slot] : kNeverChecked};
-    if (const CurvilinearTuning* curves = own_curves.find(body.slot); curves != nullptr) {
-      moved.has_curves = 1;
-      moved.curves = *curves;
-      own_curves.forget(body.slot);
-    }
     size_t box = static_cast<size_t>(owner);
     if (!reassigns) {
       const auto at = std::lower_bound(neighbours.begin(), neighbours.end(), owner);
       THRONG_ASSERT(at != neighbours.end() && *at == owner);  // No step leads farther.
       box = static_cast<size_t>(at - neighbours.begin());
     }
-    to[box].push_back(moved);
+    to[box].push_back(moved(n, shared.sub_step - 1));
+    own_curves.forget(body.slot);
     shared.names.give_slot_back(body.slot);
     body = walk.bodies().back();
     walk.engine().shrink(walk.bodies().size() - 1);
@@ -131,37 +177,18 @@ void Crowd::State::migrate() {
   } else {
     share.exchange(std::span<const std::vector<Moved>>(to), came);
   }
-  for (const Moved& moved : came) {
-    const uint32_t slot = shared.names.take_slot(moved.walker.ghost.body.slot);
-    shared.orientations.resize(shared.names.slots());
-    where.resize(shared.names.slots(), kNoBody);
-    walk.take_over(moved.walker, slot);
-    shared.orientations[slot] = moved.orientation;
-    inside.resize(std::max(inside.size(), slot + size_t{1}), 0);
-    inside[slot] = moved.inside;
-    checked_at.resize(std::max(checked_at.size(), slot + size_t{1}), kNeverChecked);
-    checked_at[slot] = moved.checked_at;
-    if (moved.has_curves != 0) own_curves.set(slot, moved.curves);
-    shared.some_leave = shared.some_leave || moved.walker.ghost.body.leaves;
-  }
+  for (const Moved& one : came) take(one, shared.sub_step - 1);
   where_is_old = true;
 }
 
+// In one message.
 void Crowd::State::gather_events(crowd::EngineCounts& counts, CrowdReport& report) {
   crowd::RankShare& share = *shared.share;
-  gather_ids(share, shared.arrived);
-  gather_ids(share, shared.goal_unreachable);
-  gather_ids(share, no_progress);
-  gather_ids(share, entered);
-  std::sort(no_progress.begin(), no_progress.end(),
-            [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
-  std::sort(entered.begin(), entered.end(), [](const AreaEntry& a, const AreaEntry& b) {
-    return a.id.slot1 != b.id.slot1 ? a.id.slot1 < b.id.slot1 : a.area < b.area;
-  });
   struct Sums {
     crowd::EngineCounts counts;
     uint64_t planned = 0, out_of_memory = 0, jam_searches = 0, changed_route = 0;
     uint64_t avatars = 0, sent_bytes = 0;
+    std::array<uint32_t, 4> events = {};  // how many of each kind follow
   };
   const Sums mine{counts,
                   shared.planned,
@@ -169,10 +196,27 @@ void Crowd::State::gather_events(crowd::EngineCounts& counts, CrowdReport& repor
                   shared.jam_searches,
                   shared.changed_route,
                   walk.bodies().size(),
-                  share.take_sent_bytes()};
+                  share.sent_bytes(),
+                  {size_of(shared.arrived), size_of(shared.goal_unreachable), size_of(no_progress),
+                   size_of(entered)}};
+  std::vector<uint8_t> bytes;
+  put_value(bytes, mine);
+  for_events([&](auto& events) {
+    for (const auto& event : events) put_value(bytes, event);
+    events.clear();
+  });
   counts = {};
   Sums all;
-  for (const Sums& of : share.gather(std::span<const Sums>(&mine, 1))) {
+  for (const RankGroup::Bytes& came : share.gather_bytes(bytes)) {
+    const std::span<const uint8_t> from(came);
+    Sums of;
+    std::memcpy(&of, from.data(), sizeof of);
+    size_t at = sizeof of, kind = 0;
+    for_events([&](auto& events) {
+      const size_t size = of.events[kind++] * sizeof(events[0]);
+      append_values(from.subspan(at, size), events);
+      at += size;
+    });
     counts.add(of.counts);
     all.planned += of.planned;
     all.out_of_memory += of.out_of_memory;
@@ -181,6 +225,11 @@ void Crowd::State::gather_events(crowd::EngineCounts& counts, CrowdReport& repor
     all.avatars = std::max(all.avatars, of.avatars);
     all.sent_bytes = std::max(all.sent_bytes, of.sent_bytes);
   }
+  std::sort(no_progress.begin(), no_progress.end(),
+            [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
+  std::sort(entered.begin(), entered.end(), [](const AreaEntry& a, const AreaEntry& b) {
+    return a.id.slot1 != b.id.slot1 ? a.id.slot1 < b.id.slot1 : a.area < b.area;
+  });
   report.ranks = share.size();
   report.most_avatars = all.avatars;
   report.sent_bytes = all.sent_bytes;

@@ -72,8 +72,23 @@ struct Crowd::State {
         mode_of_class(shared.classes.size(), nullptr) {}
 
   // crowd_share.cpp: a crowd that ranks share.
-  /// It has no avatars and classes yet. Fails with kBadConfig.
+  /// All that is known of an avatar.
+  struct Moved {
+    crowd::MovedWalker walker;
+    crowd::Orientation orientation = {};
+    uint64_t inside = 0;
+    std::array<int32_t, 3> checked_at = kNeverChecked;
+    uint32_t has_curves = 0;
+    CurvilinearTuning curves = {};
+  };
+  /// Of the n-th of the bodies. `next`: the number of the next sub-step, from 0.
+  [[nodiscard]] Moved moved(size_t n, uint64_t next) const;
+  /// Adds one to those of this rank.
+  void take(const Moved& moved, uint64_t next);
+  /// Those of all ranks, by name.
+  [[nodiscard]] std::vector<Moved> moved_everywhere() const;
   Result<void> share_with(RankGroup& group);
+  [[nodiscard]] Error share_refused(size_t avatar_class) const;
   /// Ranks share no crowd that takes off-mesh links.
   [[nodiscard]] Result<void> check_links() const;
   /// Avatars on all ranks.
@@ -89,6 +104,14 @@ struct Crowd::State {
   void migrate();
   /// What ranks found in a step becomes what all found.
   void gather_events(crowd::EngineCounts& counts, CrowdReport& report);
+  /// Calls f for each list of what happened to avatars in a step.
+  template <class F>
+  void for_events(F&& f) {
+    f(shared.arrived);
+    f(shared.goal_unreachable);
+    f(no_progress);
+    f(entered);
+  }
   /// Is its body on this rank? Where not, it forgets what all ranks know of the avatar's path.
   [[nodiscard]] crowd::Body* commanded(AvatarId id);
   [[nodiscard]] std::vector<AvatarState> own_states() const;

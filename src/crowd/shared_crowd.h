@@ -10,9 +10,10 @@
 /// Crowds that ranks share.
 namespace throng::crowd {
 
-/// An empty crowd of all ranks of a group, which stays as long as the crowd. Fails as
-/// Crowd::create, alike on all ranks, and with kBadConfig if its edits have off-mesh links.
-Result<Crowd> create_shared_crowd(const World& world, const CrowdConfig& config, RankGroup& group);
+/// Makes a crowd, which each rank has made or restored alike, one of all ranks of a group, which
+/// stays as long as the crowd. Fails, alike on all ranks, as `crowd` did, and with kBadConfig if
+/// avatars fly or go over nodes or if its edits have off-mesh links.
+Result<Crowd> share_crowd(Result<Crowd> crowd, RankGroup& group);
 /// Avatars that this rank moves.
 std::vector<AvatarState> own_avatars(const Crowd& crowd);
 

@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: MIT
 """A crowd that several processes under mpirun share: what one process does, bit for bit, for any number of them.
 
-python3 ranks_run_test.py build/release/throng"""
+python3 ranks_run_test.py build/release/throng [KILLS]"""
 import json
 import os
 import pathlib
+import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 TRIALS = pathlib.Path(__file__).resolve().parents[2] / "trials"
@@ -64,6 +67,71 @@ def test_scenarios(folder):
         assert trips[0].read_bytes() == trips[1].read_bytes(), file
 
 
+def ranks_of(launcher):
+    """The processes that a running mpirun has started, by rank."""
+    found = {}
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            parent = (entry / "stat").read_text().rpartition(")")[2].split()[1]
+            names = (entry / "environ").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        for name in names:
+            if int(parent) == launcher and name.startswith(b"OMPI_COMM_WORLD_RANK="):
+                found[int(name.partition(b"=")[2])] = int(entry.name)
+    return found
+
+
+def kill_and_resume(folder, words, one, seed):
+    """A rank dies at a random moment; the run goes on with another number of ranks. True if it was killed amid steps."""
+    chance = random.Random(seed)
+    ranks, file = chance.choice((2, 3)), folder / f"{seed}.checkpoint"
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), PROGRAM, *map(str, words), "--checkpoint", file, "--checkpoint-every",
+                           "3"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
+        deadline = time.monotonic() + 60
+        while not file.exists() and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(chance.uniform(0, 0.5))
+        victim = ranks_of(process.pid).get(chance.randrange(ranks))
+        if victim is not None and process.poll() is None:
+            os.kill(victim, signal.SIGKILL)
+        out, err = process.communicate(timeout=120)
+    if process.returncode == 0:  # It was done before.
+        assert json.loads(out)["state_hash"] == one["state_hash"], out
+        return False
+    lines = {line for line in err.splitlines() if line.startswith("throng: ")}
+    assert lines and all("ended in step" in line and f"--resume {file}" in line for line in lines), err
+    again, _ = said(run(chance.choice((1, 2, 4)), *words, "--resume", file))
+    for key in ("state_hash", "steps", "overlaps", "wall_entries"):
+        assert key == "steps" or again[key] == one[key], (seed, key, again, one)
+    return True
+
+
+def test_checkpoints(folder, kills):
+    world = folder / "city.throng"
+    assert run(1, "bake", "builtin:city,size=120,seed=3", "-o", world).returncode == 0
+    words = ["run", world, "--avatars", 300, "--steps", 150, "--near", 30, "--threads", 1, "--json"]
+    one, _ = said(run(1, *words))
+    killed = sum(kill_and_resume(folder, words, one, seed) for seed in range(1, kills + 1))
+    assert killed >= kills / 2, f"only {killed} of {kills} were killed amid steps"
+    # A checkpoint of one process, and what is refused.
+    file = folder / "alone.checkpoint"
+    short = [*words[:5], 60, *words[6:]]
+    assert run(1, *short, "--checkpoint", file, "--checkpoint-every", 50).returncode == 0
+    again, _ = said(run(3, *words, "--resume", file))
+    assert again["state_hash"] == one["state_hash"]
+    for change, word in ((["--seed", 2], "seed"), (["--near", 31], "near"), (["--avatars", 299], "avatars")):
+        done = run(1, *words, *change, "--resume", file)
+        assert done.returncode == 2 and word in done.stderr and not done.stdout, done.stderr
+    bytes_of = file.read_bytes()
+    for broken in (b"", bytes_of[:100], bytes_of[:-1], b"x" + bytes_of, bytes_of[:3000] + b"\xff" + bytes_of[3001:]):
+        (folder / "broken").write_bytes(broken)
+        done = run(1, *words, "--resume", folder / "broken")
+        assert done.returncode == 2 and "broken" in done.stderr + "crowd: broken", (broken[:40], done.stderr)
+        assert len([line for line in done.stderr.splitlines() if line.startswith("throng: ")]) == 1, done.stderr
+    return killed
+
+
 def test_refusals(folder):
     world = folder / "air.throng"
     assert run(1, "bake", "builtin:garage", "-o", world, "--fly").returncode == 0
@@ -81,10 +149,12 @@ def test_refusals(folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for test in (test_crowds, test_scenarios, test_refusals):
+        kills = int(sys.argv[2]) if len(sys.argv) > 2 else 4
+        tests = {test_crowds: [], test_scenarios: [], test_checkpoints: [kills], test_refusals: []}
+        for test, more in tests.items():
             (folder / test.__name__).mkdir()
-            test(folder / test.__name__)
-    print("equal crowds by 1, 2, 3, 4 and 7 ranks")
+            test(folder / test.__name__, *more)
+    print(f"equal crowds by 1, 2, 3, 4 and 7 ranks, and after {kills} kills")
 
 
 main()

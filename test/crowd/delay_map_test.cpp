@@ -37,11 +37,11 @@ TEST(DelayMap, AveragesExponentiallyAndForgets) {
   }
   EXPECT_TRUE(map.delays().is_slow(1));
   EXPECT_FALSE(map.delays().is_slow(0));
-  EXPECT_EQ(map.saved().size(), 1u);
+  EXPECT_EQ(map.saved(nullptr).size(), 1u);
   for (int second = 0; second < 60; ++second) pass_second(map, step);
   EXPECT_FALSE(map.delays().is_slow(1));
   EXPECT_EQ(map.delays().shares(1)[bin], GroundDelays::kFree);
-  EXPECT_TRUE(map.saved().empty());
+  EXPECT_TRUE(map.saved(nullptr).empty());
 }
 
 TEST(DelayMap, BodiesThatGetOnLeaveTheGroundFree) {
@@ -86,10 +86,10 @@ TEST(DelayMap, IsRestoredAsItWasSaved) {
     pass_second(map, step);
   }
   map.note(2, {90000, 1000}, 1, 1, 9);
-  const std::vector<DelayMap::Saved> saved = map.saved();
+  const std::vector<DelayMap::Saved> saved = map.saved(nullptr);
   ASSERT_EQ(saved.size(), 2u);
   DelayMap restored(5, 0.1);
-  ASSERT_TRUE(restored.restore(saved, map.saved_questions()));
+  ASSERT_TRUE(restored.restore(saved, map.saved_questions(nullptr)));
   EXPECT_EQ(restored.is_asked(), map.is_asked());
   for (int second = 0; second < 3; ++second) {
     uint64_t same = step;

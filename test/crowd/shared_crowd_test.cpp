@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -63,7 +65,7 @@ std::vector<Course> shared(const World& world, const CrowdConfig& config, int32_
     Course& course = courses[static_cast<size_t>(group.rank())];
     CrowdConfig own = config;
     own.edits = Edits();
-    auto crowd = crowd::create_shared_crowd(world, own, group);
+    auto crowd = crowd::share_crowd(Crowd::create(world, own), group);
     ASSERT_TRUE(crowd) << crowd.error().message;
     program(*crowd, own.edits, course);
     course.states = crowd::own_avatars(*crowd);
@@ -233,6 +235,50 @@ TEST(SharedCrowd, TakesEveryCall) {
     }
   };
   expect_same(world, {.workers = 1}, {2, 4}, program, "every call");
+}
+
+// Saved by so many ranks, restored by others or in one process: the same steps as undisturbed.
+TEST(SharedCrowd, IsSavedAndRestoredByAnyNumberOfRanks) {
+  const World& world = garage();
+  const CrowdConfig config{.workers = 1};
+  constexpr int kSteps = 60;
+  std::vector<std::set<uint64_t>> hashes(40);  // of each step, whichever ranks
+  std::mutex adding;
+  const Course whole = alone(world, config, wanders(world, 300, 2 * kSteps));
+  for (const int32_t savers : {1, 3}) {
+    std::vector<std::vector<uint8_t>> saved(static_cast<size_t>(savers));
+    test::ThreadRanks(savers).run([&](RankGroup& group) {
+      CrowdConfig own = config;
+      own.edits = Edits();
+      auto crowd = crowd::share_crowd(Crowd::create(world, own), group);
+      ASSERT_TRUE(crowd);
+      Course course;
+      wanders(world, 300, kSteps)(*crowd, own.edits, course);
+      saved[static_cast<size_t>(group.rank())] = crowd->save();
+      ASSERT_EQ(course.hashes.back(), whole.hashes[kSteps - 1]);
+    });
+    for (const auto& of_rank : saved) ASSERT_EQ(of_rank, saved[0]);
+    for (const int32_t restorers : {1, 2, 4}) {
+      test::ThreadRanks(restorers).run([&](RankGroup& group) {
+        Context context;
+        CrowdConfig own = config;
+        own.edits = Edits();
+        auto crowd = crowd::share_crowd(Crowd::restore(world, own, saved[0], context), group);
+        ASSERT_TRUE(crowd) << crowd.error().message;
+        ASSERT_EQ(crowd->state_hash(), whole.hashes[kSteps - 1]);
+        ASSERT_EQ(crowd->size(), 300u);
+        for (int step = 0; step < 40; ++step) {
+          crowd->step();
+          const uint64_t hash = crowd->state_hash();
+          const std::lock_guard lock(adding);
+          hashes[static_cast<size_t>(step)].insert(hash);
+        }
+        const CrowdCheck check = crowd->check();
+        EXPECT_EQ(check.overlaps + check.wall_entries, 0u);
+      });
+    }
+  }
+  for (const auto& of_step : hashes) EXPECT_EQ(of_step.size(), 1u);
 }
 
 // Obstacles that avatars block, that others leave, and that move.

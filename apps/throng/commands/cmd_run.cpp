@@ -98,9 +98,19 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
   run.also = *also;
-  auto crowd =
-      times.measure("prepare", [&] { return GoalCrowd::create(world, run, session.context); });
+  const std::string& resume = run.checkpoints.resume;
+  auto checkpoint = resume.empty() ? Result<Checkpoint>(Checkpoint()) : read_checkpoint(resume);
+  if (!checkpoint) return fail(checkpoint.error());
+  if (!resume.empty()) {
+    const auto ok = check_settings(*checkpoint, resume, world.summary().hash, crowd_settings(run));
+    if (!ok) return fail(ok.error());
+  }
+  auto crowd = times.measure("prepare", [&] {
+    return resume.empty() ? GoalCrowd::create(world, run, session.context)
+                          : GoalCrowd::restore(world, run, *checkpoint, session.context);
+  });
   if (!crowd) return fail(crowd.error());
+  *checkpoint = {};
   if (auto ok = check_memory(options, "the crowd and its paths were made"); !ok) {
     return fail(ok.error());
   }
@@ -137,8 +147,8 @@ Result<void> check_scenario(const CLI::App& command, const std::string& file) {
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world; in {} write {}", name, file, key)};
   }
-  for (const char* name :
-       {"--wander", "--near", "--set", "--order", "--axes", "--set-at", "--memory"}) {
+  for (const char* name : {"--wander", "--near", "--set", "--order", "--axes", "--set-at",
+                           "--memory", "--checkpoint", "--resume"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
@@ -174,9 +184,10 @@ Result<void> check_wander(const CLI::App& command, const char* remedy = "leave o
   if (rank_info().size > 1) {
     return Error{Errc::kBadConfig, "--wander is for one process; start it without mpirun"};
   }
-  for (const char* name : {"--goals", "--near", "--radius", "--labels", "--zones",
-                           "--search-memory", "--model", "--memory", "--set", "--order", "--axes",
-                           "--set-at", "--full-speed", "--ignore-jams", "--pushing"}) {
+  for (const char* name :
+       {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
+        "--memory", "--set", "--order", "--axes", "--set-at", "--full-speed", "--ignore-jams",
+        "--pushing", "--checkpoint", "--resume"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig, fmt::format("{} is for avatars with goals; {}", name, remedy)};
   }
@@ -231,6 +242,20 @@ int run(Session& session, RunOptions& options) {
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
   return run_wanderers(session, *world, wander_run(options, *also), times);
+}
+
+void add_checkpoints(CLI::App& command, Session& session, CheckpointOptions& checkpoints) {
+  add_output(command, session, "--checkpoint", checkpoints.write,
+             "Save the run in this file, again and again, so that it can go on if it is ended")
+      ->type_name("FILE");
+  command.add_option("--checkpoint-every", checkpoints.every, "Save it after each K-th step")
+      ->check(above(0))
+      ->capture_default_str();
+  command
+      .add_option("--resume", checkpoints.resume,
+                  "Go on from a checkpoint, with the options of its run and any number of ranks; "
+                  "files hold the steps from there on")
+      ->type_name("FILE");
 }
 
 }  // namespace
@@ -304,6 +329,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--every", options->sinks.every, "Write each K-th step")
       ->check(above(0))
       ->capture_default_str();
+  add_checkpoints(*command, session, options->crowd.checkpoints);
   command->add_option("--check-every", options->check_every,
                       "Check for walls entered and overlaps each K-th step, 0: ten times a run");
   add_output(*command, session, "--trips", options->trips,

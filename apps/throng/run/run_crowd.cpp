@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "input_file.h"
+#include "run/rerun.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/world.h"
@@ -151,6 +152,18 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
           rank_text(t));
 }
 
+// If another rank dies, this one is ended while it waits for it.
+void set_last_words(const CrowdRun& run, uint64_t step, std::optional<uint64_t> saved_at) {
+  if (rank_info().size <= 1) return;
+  const std::string& file =
+      run.checkpoints.write.empty() ? run.checkpoints.resume : run.checkpoints.write;
+  const std::string remedy =
+      saved_at ? fmt::format("go on from step {} with --resume {}", *saved_at, file)
+               : std::string("start it again; with --checkpoint FILE it can go on");
+  last_words(fmt::format("run: ended in step {}, by a signal or because a rank has died; {}", step,
+                         remedy));
+}
+
 }  // namespace
 
 Result<void> read_goals(CrowdRun& run) {
@@ -165,6 +178,34 @@ GoalCrowd::GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd)
     : world_(world), run_(run), crowd_(std::move(crowd)) {}
 
 Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Context& context) {
+  return create(world, run, nullptr, context);
+}
+
+Result<GoalCrowd> GoalCrowd::restore(const World& world, const CrowdRun& run,
+                                     const Checkpoint& checkpoint, Context& context) {
+  return create(world, run, &checkpoint, context);
+}
+
+Checkpoint GoalCrowd::checkpoint(const Json& settings) const {
+  return {.step = steps_,
+          .settings = settings,
+          .world = world_.summary().hash,
+          .given = given_,
+          .crowd = crowd_.save()};
+}
+
+Result<void> GoalCrowd::add_restored(const std::string& class_name, uint32_t count) {
+  const Result<int32_t> avatar_class = class_named(world_, class_name);
+  if (!avatar_class) return avatar_class.error();
+  class_of_.resize(class_of_.size() + count, *avatar_class);
+  while (all_.size() < class_of_.size()) {  // No avatar is ever removed.
+    all_.push_back({.slot1 = static_cast<uint32_t>(all_.size() + 1), .generation = 1});
+  }
+  return {};
+}
+
+Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run,
+                                    const Checkpoint* checkpoint, Context& context) {
   CrowdRun with_nodes = run;
   const std::vector<AvatarClass> classes = world.summary().classes;
   std::vector<AvatarGroup> groups = run.also;
@@ -183,11 +224,15 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
     if (!nodes) return nodes.error();
     with_nodes.config.nodes = *std::move(nodes);
   }
-  auto crowd = crowd_over_ranks(world, with_nodes.config);
+  auto crowd = checkpoint == nullptr
+                   ? crowd_over_ranks(world, with_nodes.config)
+                   : restore_over_ranks(world, with_nodes.config, checkpoint->crowd, context);
   if (!crowd) return crowd.error();
   GoalCrowd made(world, with_nodes, std::move(*crowd));
   for (const auto& [name, count] : groups) {
-    if (auto ok = made.scatter(name, count, context); !ok) return ok.error();
+    const auto ok =
+        checkpoint == nullptr ? made.scatter(name, count, context) : made.add_restored(name, count);
+    if (!ok) return ok.error();
   }
   for (const SetChange& change : run.set_changes) {
     if (change.avatar.value_or(0) < made.all_.size()) continue;
@@ -196,7 +241,15 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
   }
   if (auto ok = made.read_places(); !ok) return ok.error();
   made.given_.resize(made.class_of_.size());
-  made.give(made.all_);
+  if (checkpoint != nullptr) {
+    if (checkpoint->given.size() != made.given_.size() || made.crowd_.size() != made.all_.size()) {
+      return Error{Errc::kBadFile, "the checkpoint has other avatars; start the run again"};
+    }
+    made.given_ = checkpoint->given;
+    made.steps_ = checkpoint->step;
+  } else {
+    made.give(made.all_);
+  }
   return made;
 }
 
@@ -389,9 +442,18 @@ int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes&
   const auto write = [&](uint64_t step) {
     return times.measure("write", [&] { return shown(step); });
   };
-  if (auto ok = write(0); !ok) return fail(ok.error());
+  std::optional<uint64_t> saved_at;
+  if (!run.checkpoints.resume.empty()) saved_at = crowd.steps();
+  const auto save = [&]() -> Result<void> {
+    const Checkpoint checkpoint = crowd.checkpoint(crowd_settings(run));
+    Result<void> ok;
+    if (rank_info().rank == 0) ok = write_checkpoint(run.checkpoints.write, checkpoint);
+    return agree_over_ranks(ok);
+  };
+  if (auto ok = write(crowd.steps()); !ok) return fail(ok.error());
   Totals totals;
-  for (uint64_t step = 1; step <= run.steps; ++step) {
+  for (uint64_t step = crowd.steps() + 1; step <= run.steps; ++step) {
+    set_last_words(run, step, saved_at);
     const CrowdReport report = crowd.step();
     totals.add(report);
     add_step(report, times);
@@ -400,9 +462,14 @@ int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes&
       totals.add(times.measure("check", [&] { return crowd.crowd().check(); }));
     }
     if (auto ok = write(step); !ok) return fail(ok.error());
+    if (!run.checkpoints.write.empty() && step % run.checkpoints.every == 0) {
+      if (auto ok = times.measure("checkpoint", save); !ok) return fail(ok.error());
+      saved_at = step;
+    }
     show_progress(session, "walk", step, run.steps);
     if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
   }
+  last_words({});
   if (auto ok = times.measure("write", finished); !ok) return fail(ok.error());
   print(session, run, crowd.crowd(), totals, times);
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;

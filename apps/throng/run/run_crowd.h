@@ -11,6 +11,7 @@
 #include "command.h"
 #include "run/avatar_group.h"
 #include "run/caacd_options.h"
+#include "run/checkpoint.h"
 #include "run/run_times.h"
 #include "throng/crowd.h"
 #include "throng/surface.h"
@@ -33,6 +34,7 @@ struct CrowdRun {
   std::vector<double> part = {};       // x0, z0, x1, z1 of a district; empty: the whole world [m]
   std::vector<SetChange> set_changes;  // in the order in which they are made
   CrowdConfig config;
+  CheckpointOptions checkpoints;
 };
 
 /// Fills in goals_text. Fails with kNotFound.
@@ -44,13 +46,22 @@ Result<void> read_goals(CrowdRun& run);
 class GoalCrowd {
  public:
   static Result<GoalCrowd> create(const World& world, const CrowdRun& run, Context& context);
+  /// As it was when a checkpoint was taken, of a run with the same settings.
+  static Result<GoalCrowd> restore(const World& world, const CrowdRun& run,
+                                   const Checkpoint& checkpoint, Context& context);
+  /// Between two steps; `settings` are of its run.
+  [[nodiscard]] Checkpoint checkpoint(const Json& settings) const;
   CrowdReport step();
   /// Gives new goals to avatars that arrived in the last step, or found no path.
   void give_goals();
   [[nodiscard]] const Crowd& crowd() const { return crowd_; }
+  [[nodiscard]] uint64_t steps() const { return steps_; }
 
  private:
   GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd);
+  static Result<GoalCrowd> create(const World& world, const CrowdRun& run,
+                                  const Checkpoint* checkpoint, Context& context);
+  Result<void> add_restored(const std::string& class_name, uint32_t count);
   Result<void> scatter(const std::string& class_name, uint32_t count, Context& context);
   Result<void> read_places();
   [[nodiscard]] bool goes_over_nodes(int32_t avatar_class) const;

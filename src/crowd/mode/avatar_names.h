@@ -21,8 +21,12 @@ class AvatarNames {
   static constexpr uint32_t kNowhere = UINT32_MAX;
   static constexpr uint32_t kNone = UINT32_MAX - 1;
 
-  /// From now on ranks share the crowd, which has no avatar yet.
-  void share() { is_shared_ = true; }
+  /// From now on ranks share the crowd, and all avatars are elsewhere: no slot is taken.
+  void share() {
+    is_shared_ = true;
+    slot_of_.assign(generation_.size(), kNowhere);
+    for (const uint32_t name : free_) slot_of_[name] = kNone;
+  }
   [[nodiscard]] bool is_shared() const { return is_shared_; }
 
   /// Names an avatar that is added; on all ranks.

@@ -52,6 +52,7 @@ void ColumnOwners::for_columns_around(uint32_t column, F&& f) const {
 }
 
 void ColumnOwners::find_neighbours() {
+  ++version_;
   neighbours_.clear();
   is_at_border_.assign(owners_.size(), false);
   for (uint32_t column = 0; column < owners_.size(); ++column) {

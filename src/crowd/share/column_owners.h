@@ -31,6 +31,8 @@ class ColumnOwners {
   [[nodiscard]] int32_t tiles() const { return 1 << (bits_ - kTileUnitBits); }
 
   void set_owners(std::vector<int32_t> owners);
+  /// Another one after each change of owners or reach.
+  [[nodiscard]] uint64_t version() const { return version_; }
   /// Bodies that far off matter to each other. [units]
   void set_reach(int32_t reach);
   /// Ranks that own something so near to what this one owns that bodies there may matter to each
@@ -51,6 +53,7 @@ class ColumnOwners {
   int32_t bits_ = kTileUnitBits;  // of the units along a side
   int32_t wide_ = 0, deep_ = 0;   // columns
   int32_t reach_ = 0;
+  uint64_t version_ = 0;
   std::vector<int32_t> owners_;
   std::vector<bool> is_at_border_;  // of columns of this rank
   std::vector<int32_t> neighbours_;

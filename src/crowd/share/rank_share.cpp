@@ -18,6 +18,16 @@ uint64_t RankShare::sum(uint64_t mine) {
   return sum;
 }
 
+std::span<const RankGroup::Bytes> RankShare::gather_bytes(std::span<const uint8_t> mine) {
+  if (size() > 1) sent_bytes_ += mine.size();
+  return group_.gather(mine);
+}
+
+std::span<const RankGroup::Bytes> RankShare::exchange_bytes(std::span<const RankGroup::Bytes> to) {
+  for (const RankGroup::Bytes& bytes : to) sent_bytes_ += bytes.size();
+  return group_.exchange(owners_.neighbours(), to);
+}
+
 float RankShare::largest(float mine) {
   const std::vector<float> all = gather(std::span<const float>(&mine, 1));
   return *std::max_element(all.begin(), all.end());

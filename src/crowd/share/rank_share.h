@@ -32,11 +32,13 @@ class RankShare {
 
   // All ranks call these alike.
 
-  /// What all have, by rank.
+  /// What all have, by rank. Stays until the next call.
+  [[nodiscard]] std::span<const RankGroup::Bytes> gather_bytes(std::span<const uint8_t> mine);
+  /// The same as values, one after the other.
   template <class T>
   [[nodiscard]] std::vector<T> gather(std::span<const T> mine) {
     std::vector<T> all;
-    for (const RankGroup::Bytes& bytes : group_.gather(bytes_of_span(mine))) {
+    for (const RankGroup::Bytes& bytes : gather_bytes(bytes_of_span(mine))) {
       append_values(std::span<const uint8_t>(bytes), all);
     }
     return all;
@@ -52,6 +54,8 @@ class RankShare {
     const std::vector<T> all = gather(own);
     return all.empty() ? std::nullopt : std::optional<T>(all.front());
   }
+  /// Sends bytes to each of owners().neighbours(), and returns theirs. Stays until the next call.
+  std::span<const RankGroup::Bytes> exchange_bytes(std::span<const RankGroup::Bytes> to);
   /// What neighbours have for this rank, in their order. `to`: for each of owners().neighbours().
   template <class T>
   std::span<const T> exchange(std::span<const std::vector<T>> to, std::vector<T>& from) {
@@ -59,10 +63,9 @@ class RankShare {
     for (size_t n = 0; n < to.size(); ++n) {
       const auto bytes = bytes_of_span(std::span<const T>(to[n]));
       outgoing_[n].assign(bytes.begin(), bytes.end());
-      sent_bytes_ += bytes.size();
     }
     from.clear();
-    for (const RankGroup::Bytes& bytes : group_.exchange(owners_.neighbours(), outgoing_)) {
+    for (const RankGroup::Bytes& bytes : exchange_bytes(outgoing_)) {
       append_values(std::span<const uint8_t>(bytes), from);
     }
     return from;
@@ -77,6 +80,7 @@ class RankShare {
       others.push_back(rank);
       const auto bytes = bytes_of_span(std::span<const T>(to[static_cast<size_t>(rank)]));
       outgoing_.emplace_back(bytes.begin(), bytes.end());
+      sent_bytes_ += bytes.size();
     }
     std::vector<T> from;
     for (const RankGroup::Bytes& bytes : group_.exchange(others, outgoing_)) {
@@ -88,8 +92,9 @@ class RankShare {
   /// Assigns the columns to the ranks, by these bodies of this one and those of the others.
   void assign_columns(std::span<const Body> bodies);
 
-  /// To neighbours, since it was asked last.
-  [[nodiscard]] uint64_t take_sent_bytes() { return std::exchange(sent_bytes_, 0); }
+  /// By this rank, since they were forgotten. What all gather counts once.
+  [[nodiscard]] uint64_t sent_bytes() const { return sent_bytes_; }
+  void forget_sent_bytes() { sent_bytes_ = 0; }
 
  private:
   RankGroup& group_;

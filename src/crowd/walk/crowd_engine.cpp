@@ -192,19 +192,19 @@ Plane CrowdEngine::preferred_of(const Body& body, float detour_angle) const {
   return steer::preferred_towards(left, speed, dt, detour_angle);
 }
 
-void CrowdEngine::prefer_all(uint64_t step, Before before) {
+// To the right, if only other bodies block it. At a wall or a corner that would press a crowd
+// against it: there, to a random side.
+float CrowdEngine::turned_aside(const Body& b) const {
   constexpr float kSide = 2;  // [s] for which a body keeps to a side
-  const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
-  // To the right, if only other bodies block it. At a wall or a corner that would press a crowd
-  // against it: there, to a random side.
-  const auto turn = [&](const Body& b) {
-    if (b.in_counterflow || !is_blocked_by_walls(b)) return b.detour_angle;
-    if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) <
-        kCornerRadius)
-      return 0.0f;
-    const bool left = (random_u64(config_.seed ^ kSides, name_of(b), window) & 1) != 0;
-    return left ? -b.detour_angle : b.detour_angle;
-  };
+  if (b.in_counterflow || !is_blocked_by_walls(b)) return b.detour_angle;
+  const Plane left = config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
+  if (size_of(left) < kCornerRadius) return 0;
+  const auto window = step_ / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
+  const bool is_left = (random_u64(config_.seed ^ kSides, name_of(b), window) & 1) != 0;
+  return is_left ? -b.detour_angle : b.detour_angle;
+}
+
+void CrowdEngine::prefer_all(uint64_t step, Before before) {
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
   const auto run = [&](size_t piece, int32_t worker) {
     const size_t begin = piece * kGrain;
@@ -216,8 +216,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     before(bodies, worker);
     for (Body& b : bodies) {
       if (!config_.slope_factors.empty()) slow_on_slope(b);
-      if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
-      b.preferred = preferred_of(b, turn(b));
+      if (finds_preferred(b)) b.preferred = preferred_of(b, turned_aside(b));
     }
   };
   parallel_for_worker(pieces, config_.workers, run);
@@ -595,7 +594,7 @@ void CrowdEngine::resolve_conflicts(uint64_t step) {
                    propose(i, scratch, round);
                    return false;
                  });
-    if (exchange_ != nullptr) exchange_moves();
+    if (exchange_ != nullptr) exchange_moves(round);
     for_contests(&Contests::open, [&](uint32_t i, Worker&) {
       const bool decided = proposals()[i].round == round && is_accepted(i, step);
       if (decided) bodies_[i].state = Body::kDecided;

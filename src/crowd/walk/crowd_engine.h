@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/arrays/huge_array.h"
+#include "core/arrays/release.h"
 #include "core/function_ref.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
@@ -116,6 +117,11 @@ class CrowdEngine {
   /// What it chose when it last decided: a body that another engine moves from now on takes it
   /// along. [m/s]
   [[nodiscard]] steer::Plane choice(uint32_t slot) const { return choices_[slot]; }
+  /// Does its preferred velocity follow from all else that a ghost has?
+  [[nodiscard]] static bool finds_preferred(const Body& body) {
+    return !body.has(Body::kExternal) && !body.has(Body::kMovedElsewhere) && body.steps > 0;
+  }
+  [[nodiscard]] StepUnits units() const { return config_.units; }
   /// Moves a body from now on, as it was before a step, that another engine has moved.
   void take_over(const Ghost& ghost, steer::Plane choice, uint64_t step);
   /// How far bodies see, at most. [units]
@@ -135,6 +141,11 @@ class CrowdEngine {
     choices_.resize(rows);
     if (!config_.queues) return;
     for (auto& requests : requests_) requests.resize(rows);
+  }
+  void forget_rows() {
+    release(progress_);
+    release(choices_);
+    for (auto& requests : requests_) release(requests);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
@@ -280,6 +291,7 @@ class CrowdEngine {
   [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
   void slow_down(Body& body, float level_speed, float factor);
   void slow_on_slope(Body& body);
+  [[nodiscard]] float turned_aside(const Body& body) const;
   void prefer_all(uint64_t step, Before before);
   void decide_all(EngineCounts& counts);
   bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
@@ -431,7 +443,7 @@ class CrowdEngine {
     uint32_t name = 0, body = 0;
   };
   [[nodiscard]] const Shared* find_ghost(uint32_t name) const;
-  void exchange_moves();
+  void exchange_moves(uint8_t round);
   void exchange_accepted(uint8_t round);
   void drop_ghosts();
   void resolve_conflicts(uint64_t step);

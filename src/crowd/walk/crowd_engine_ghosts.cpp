@@ -39,6 +39,8 @@ void CrowdEngine::add_ghosts(std::span<const Ghost> ghosts) {
     body.is_ghost = true;
     body.is_shown = false;
     add_with_rows(body, ghost, step_);
+    if (finds_preferred(body))
+      bodies_[size_ - 1].preferred = preferred_of(body, turned_aside(body));
   }
 }
 
@@ -62,11 +64,12 @@ const CrowdEngine::Shared* CrowdEngine::find_ghost(uint32_t name) const {
   return found != ghosts_.end() && found->name == name ? &*found : nullptr;
 }
 
-void CrowdEngine::exchange_moves() {
+void CrowdEngine::exchange_moves(uint8_t round) {
   moves_.clear();
   for (const auto& [name, i] : shown_) {
     if (bodies_[i].state != Body::kUndecided) continue;
     const Proposal& proposal = proposals()[i];
+    if (round > 1 && proposal.round != round) continue;  // They know it from an earlier round.
     moves_.push_back({.name = name, .round = proposal.round, .place = proposal.place});
   }
   for (const GhostMove& move : exchange_->exchange_moves(moves_)) {

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
+#include <vector>
 
+#include "core/files/var_number.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "world/tile_grid.h"
@@ -54,35 +57,36 @@ void DelayMap::note(uint32_t level, world::GroundPoint at, int64_t dx, int64_t d
   is_live_[level].store(1, std::memory_order_relaxed);
 }
 
-// Of each level that has some: its number, which bins, and the sums of these.
+// Of each level that has some: its number less the one before, which bins, and the sums of these.
 void DelayMap::gather_sums(uint64_t first, uint64_t last, RankShare& share) {
   static_assert(kBins <= 64);
-  std::vector<uint32_t> words;
+  std::vector<uint8_t> bytes;
+  uint64_t before = first;
   for (uint64_t level = first; level < last; ++level) {
     if (is_live_[level].load(std::memory_order_relaxed) == 0) continue;
-    const size_t begin = words.size();
     uint64_t bins = 0;
-    words.insert(words.end(), {static_cast<uint32_t>(level), 0, 0});
     for (size_t bin = 0; bin < kBins; ++bin) {
-      const uint32_t sum = sums_[level * kBins + bin].exchange(0, std::memory_order_relaxed);
-      if (sum == 0) continue;
-      bins |= uint64_t{1} << bin;
-      words.push_back(sum);
+      const bool is_noted = sums_[level * kBins + bin].load(std::memory_order_relaxed) != 0;
+      bins |= uint64_t{is_noted} << bin;
     }
-    if (bins == 0) words.resize(begin);
     if (bins == 0) continue;
-    words[begin + 1] = static_cast<uint32_t>(bins);
-    words[begin + 2] = static_cast<uint32_t>(bins >> 32);
-  }
-  const std::vector<uint32_t> all = share.gather(std::span<const uint32_t>(words));
-  for (size_t at = 0; at + 3 <= all.size();) {
-    const size_t level = all[at];
-    uint64_t bins = uint64_t{all[at + 2]} << 32 | all[at + 1];
-    at += 3;
-    is_live_[level].store(1, std::memory_order_relaxed);
+    put_number(bytes, level - std::exchange(before, level));
+    put_number(bytes, bins);
     for (; bins != 0; bins &= bins - 1) {
       const auto bin = static_cast<size_t>(std::countr_zero(bins));
-      sums_[level * kBins + bin].fetch_add(all[at++], std::memory_order_relaxed);
+      put_number(bytes, sums_[level * kBins + bin].exchange(0, std::memory_order_relaxed));
+    }
+  }
+  for (const RankGroup::Bytes& came : share.gather_bytes(bytes)) {
+    uint64_t level = first;
+    for (size_t at = 0; at < came.size();) {
+      level += take_number(came, at).value_or(0);
+      is_live_[level].store(1, std::memory_order_relaxed);
+      for (uint64_t bins = take_number(came, at).value_or(0); bins != 0; bins &= bins - 1) {
+        const auto bin = static_cast<size_t>(std::countr_zero(bins));
+        sums_[level * kBins + bin].fetch_add(
+            static_cast<uint32_t>(take_number(came, at).value_or(0)), std::memory_order_relaxed);
+      }
     }
   }
 }
@@ -138,7 +142,7 @@ bool DelayMap::ask(uint64_t seed, uint32_t name, uint64_t step) {
          (asked_ <= limit_ || random_u64(seed ^ kAsking, name, step) % asked_ < limit_);
 }
 
-std::vector<DelayMap::Saved> DelayMap::saved() const {
+std::vector<DelayMap::Saved> DelayMap::saved(RankShare* share) const {
   std::vector<Saved> saved;
   for (uint32_t level = 0; level < delays_.levels(); ++level) {
     if (is_live_[level].load(std::memory_order_relaxed) == 0) continue;
@@ -149,11 +153,32 @@ std::vector<DelayMap::Saved> DelayMap::saved() const {
       one.sums[bin] = sums_[level * kBins + bin].load(std::memory_order_relaxed);
     }
   }
+  if (share == nullptr) return saved;
+  // All have the same shares.
+  std::vector<Saved> all = share->gather(std::span<const Saved>(saved));
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Saved& a, const Saved& b) { return a.level < b.level; });
+  saved.clear();
+  for (const Saved& one : all) {
+    if (saved.empty() || saved.back().level != one.level) {
+      saved.push_back(one);
+      continue;
+    }
+    for (size_t bin = 0; bin < kBins; ++bin) saved.back().sums[bin] += one.sums[bin];
+  }
   return saved;
 }
 
-DelayMap::SavedQuestions DelayMap::saved_questions() const {
-  return {asked_, asking_.load(std::memory_order_relaxed), limit_};
+DelayMap::SavedQuestions DelayMap::saved_questions(RankShare* share) const {
+  const uint32_t mine = asking_.load(std::memory_order_relaxed);
+  return {asked_, share != nullptr ? static_cast<uint32_t>(share->sum(mine)) : mine, limit_};
+}
+
+void DelayMap::forget_sums() {
+  asking_.store(0, std::memory_order_relaxed);
+  for (size_t n = 0; n < delays_.levels() * kBins; ++n) {
+    sums_[n].store(0, std::memory_order_relaxed);
+  }
 }
 
 bool DelayMap::restore(std::span<const Saved> saved, const SavedQuestions& questions) {

@@ -77,8 +77,11 @@ class DelayMap {
   struct SavedQuestions {
     uint32_t asked = 0, asking = 0, limit = 0, unused = 0;
   };
-  [[nodiscard]] std::vector<Saved> saved() const;
-  [[nodiscard]] SavedQuestions saved_questions() const;
+  /// Of what all ranks noted that share a crowd; null: none does.
+  [[nodiscard]] std::vector<Saved> saved(RankShare* share) const;
+  [[nodiscard]] SavedQuestions saved_questions(RankShare* share) const;
+  /// Another rank has what was noted since the last average.
+  void forget_sums();
   /// False: no map of this world can have saved this.
   bool restore(std::span<const Saved> saved, const SavedQuestions& questions);
 

@@ -41,7 +41,8 @@ class StepExchange {
   /// Once all bodies know what they prefer: marks those that others must see
   /// (CrowdEngine::show_to_others), and returns those that this engine must see.
   virtual std::span<const Ghost> exchange_bodies(CrowdEngine& engine) = 0;
-  /// What those shown propose in a round, and which ghosts propose what.
+  /// What those shown propose: in the first round all that are undecided, then those that propose
+  /// another place. And which ghosts do.
   virtual std::span<const GhostMove> exchange_moves(std::span<const GhostMove> shown) = 0;
   /// Names of those whose moves were accepted in a round.
   virtual std::span<const uint32_t> exchange_accepted(std::span<const uint32_t> shown) = 0;

@@ -170,7 +170,7 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
   if (exchange_) exchange_->begin();
-  engine_.step(next_step(),
+  engine_.step(this_step(),
                has_plans ? CrowdEngine::Before(plan_all) : CrowdEngine::Before(plan_none), counts,
                times, exchange_.get());
   if (exchange_) exchange_->end();

@@ -101,12 +101,14 @@ class WalkMode final : public Mode {
   [[nodiscard]] bool aside_is_sound() const;
 
   // walk_share.cpp: a crowd that ranks share.
-  /// Of a crowd without avatars: from now on they do.
+  /// From now on they do. There is no body left, and rows are forgotten.
   void share();
-  /// What another rank needs to go on with the n-th of bodies().
-  [[nodiscard]] MovedWalker moved(size_t n) const;
+  /// What another rank needs to go on with the n-th of bodies(). `next`: of the engine's steps.
+  [[nodiscard]] MovedWalker moved(size_t n, uint64_t next) const;
   /// Goes on with it, in a slot of its own.
-  void take_over(const MovedWalker& walker, uint32_t slot);
+  void take_over(const MovedWalker& walker, uint32_t slot, uint64_t next);
+  /// What all ranks know of those that stand aside becomes the same. Of a crowd that they share.
+  [[nodiscard]] std::vector<StandsAside> standing_aside_everywhere() const;
   /// Another rank has the body: what all ranks know of its path is out of date.
   void forget_path(uint32_t name) { yielding_.erase(name); }
 
@@ -225,8 +227,8 @@ class WalkMode final : public Mode {
   [[nodiscard]] bool tries_path_again(Body& body);
 
   // walk_share.cpp
-  /// The number of the next step of the engine.
-  [[nodiscard]] uint64_t next_step() const { return shared_.sub_step - 1; }
+  /// The number of the engine's step that is being made.
+  [[nodiscard]] uint64_t this_step() const { return shared_.sub_step - 1; }
   /// Makes rows for all slots.
   void fit_rows();
   /// Adds the bodies of other ranks that matter to those which stand aside, behind its own.

@@ -9,6 +9,7 @@
 
 #include "crowd/mode/shared_state.h"
 #include "crowd/walk/delay_map.h"
+#include "crowd/walk/ghost_codec.h"
 #include "crowd/walk/routes.h"
 #include "crowd/walk/step_exchange.h"
 #include "steer/sampled.h"
@@ -25,6 +26,28 @@ struct MovedWalker {
 };
 static_assert(std::is_trivially_copyable_v<MovedWalker>);
 
+/// Rows by name, as WalkMode::save writes them, of avatars that several ranks have.
+class SavedWalkers {
+ public:
+  explicit SavedWalkers(size_t names)
+      : routes_(names),
+        progress_(names),
+        level_speeds_(names),
+        queue_(names),
+        choices_(names),
+        requests_(names) {}
+  void add(const MovedWalker& walker);
+  void save(bool queues, std::vector<uint8_t>& out) const;
+
+ private:
+  std::vector<Route> routes_;
+  std::vector<PathProgress> progress_;
+  std::vector<float> level_speeds_;
+  std::vector<QueueProgress> queue_;
+  std::vector<steer::Plane> choices_;
+  std::vector<RoomRequest> requests_;
+};
+
 /// Of the ranks that share a crowd, each with an engine.
 class RankExchange final : public StepExchange {
  public:
@@ -39,19 +62,21 @@ class RankExchange final : public StepExchange {
   std::span<const uint32_t> exchange_accepted(std::span<const uint32_t> shown) override;
 
  private:
-  template <class T, class Name>
-  std::span<const T> send_shown(std::span<const T> all, Name name_of,
-                                std::vector<std::vector<T>>& to, std::vector<T>& from);
+  /// One on the other side of the border to a neighbour.
+  struct Neighbour {
+    std::vector<Ghost> shown, seen;  // by name
+    GhostCodec of_shown, of_seen;
+  };
+  std::span<const RankGroup::Bytes> send();
 
   SharedState& shared_;
+  std::vector<Neighbour> neighbours_;
+  uint64_t version_ = 0;  // of the columns' owners
   std::vector<uint32_t> near_;
-  std::vector<std::vector<uint32_t>> shown_;  // to each neighbour: names, in order
-  std::vector<std::vector<Ghost>> bodies_;    // for each
-  std::vector<std::vector<GhostMove>> moves_;
-  std::vector<std::vector<uint32_t>> accepted_;
+  std::vector<RankGroup::Bytes> outgoing_;  // to each
   std::vector<Ghost> ghosts_;
-  std::vector<GhostMove> ghost_moves_;
-  std::vector<uint32_t> ghosts_accepted_;
+  std::vector<GhostMove> moves_;
+  std::vector<uint32_t> names_;
   std::vector<uint32_t> slots_;  // of ghosts
 };
 

@@ -424,6 +424,10 @@ class THRONG_API Crowd {
   void read(std::vector<AvatarState>& out) const;
   /// Reads one avatar. Empty if the id is unknown.
   [[nodiscard]] std::optional<AvatarState> read(AvatarId id) const;
+  /// The same, but also empty if another rank moves it (crowd_over_ranks): no message is sent, so
+  /// ranks may call it differently. Commands for such an avatar are that rank's to carry out, so a
+  /// place that depends on where it is need not be known here.
+  [[nodiscard]] std::optional<AvatarState> read_here(AvatarId id) const;
   /// The avatars that arrived in the last step, in order of slot.
   [[nodiscard]] std::span<const AvatarId> arrived() const;
   /// The avatars whose goals were dropped in the last step because no path leads there, in order of

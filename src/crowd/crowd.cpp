@@ -269,7 +269,10 @@ void Crowd::read(std::vector<AvatarState>& out) const {
 }
 
 std::optional<AvatarState> Crowd::read(AvatarId id) const {
-  if (state_->shared.share) return state_->state_everywhere(id);
+  return state_->shared.share ? state_->state_everywhere(id) : read_here(id);
+}
+
+std::optional<AvatarState> Crowd::read_here(AvatarId id) const {
   const crowd::Body* body = state_->body(id);
   if (body == nullptr) return std::nullopt;
   return state_->mode_of(*body).state_of(*body);

@@ -72,8 +72,11 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   }
   if (mode_of_class[c] != nullptr) return {};
   if (shared.share && (shared.flies(c) || shared.climbs(c))) return share_refused(c);
+  const auto is_near = [&](int32_t x, int32_t z) { return shared.share->owners().is_near(x, z); };
+  const crowd::CrowdGround::IsNear near(is_near);
   auto ground = crowd::CrowdGround::create(data, static_cast<int32_t>(shared.baked_class(c)),
-                                           world::step_mm(shared.body_class(c)));
+                                           world::step_mm(shared.body_class(c)),
+                                           shared.share ? &near : nullptr);
   if (!ground) return ground.error();
   shared.classes[c] = std::make_unique<crowd::SharedClass>();
   shared.classes[c]->ground = std::move(*ground);

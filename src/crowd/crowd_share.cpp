@@ -139,6 +139,17 @@ std::vector<Crowd::State::Moved> Crowd::State::moved_everywhere() const {
   return all;
 }
 
+// Where columns have other owners.
+void Crowd::State::keep_near_ground() {
+  const crowd::ColumnOwners& owners = shared.share->owners();
+  if (near_version == owners.version()) return;
+  near_version = owners.version();
+  for (const auto& of : shared.classes) {
+    if (!of) continue;
+    of->ground.keep_near([&](int32_t x, int32_t z) { return owners.is_near(x, z); });
+  }
+}
+
 void Crowd::State::migrate() {
   crowd::RankShare& share = *shared.share;
   share.set_reach(walk.engine().sight());
@@ -149,6 +160,7 @@ void Crowd::State::migrate() {
     assigned_at = shared.step;
     is_uneven = false;
   }
+  keep_near_ground();
   const std::span<const int32_t> neighbours = share.owners().neighbours();
   std::vector<std::vector<Moved>> to(reassigns ? static_cast<size_t>(share.size())
                                                : neighbours.size());

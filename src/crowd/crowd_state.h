@@ -61,7 +61,8 @@ struct Crowd::State {
   mutable std::vector<AvatarState> everywhere;  // since the last step, once they were asked for
   size_t assigned_for = 0;
   uint64_t assigned_at = 0;
-  bool is_uneven = false;  // They are assigned again.
+  bool is_uneven = false;     // They are assigned again.
+  uint64_t near_version = 0;  // of the owners for which grounds were kept
 
   State(const World& world, const CrowdConfig& config, crowd::MoveConfig move)
       : shared(world, config),
@@ -100,6 +101,7 @@ struct Crowd::State {
   /// Which of these would overlap an avatar of any rank?
   [[nodiscard]] std::vector<uint8_t> find_blocked(std::span<const crowd::NewAvatar> avatars,
                                                   int32_t widest) const;
+  void keep_near_ground();
   /// Avatars go to the ranks that own where they are. Before a sub-step.
   void migrate();
   /// What ranks found in a step becomes what all found.

@@ -371,10 +371,16 @@ void GoalCrowd::give(std::span<const AvatarId> ids) {
   on_nodes_.clear();
   goals_.clear();
   goals_on_nodes_.clear();
-  if (run_.near > 0) crowd_.read(states_);
   for (const AvatarId id : ids) {
-    const uint32_t slot = id.slot1 - 1;  // No avatar is removed: slots index states.
-    const Vec3d from = run_.near > 0 ? states_[slot].position : Vec3d{};
+    const uint32_t slot = id.slot1 - 1;
+    const auto here = crowd_.read_here(id);
+    if (!here) {  // Another rank gives it a goal; what is given to it is forgotten on all.
+      ++given_[slot];
+      goals_.emplace_back();
+      on_ground_.push_back(id);
+      continue;
+    }
+    const Vec3d from = here->position;
     if (places_.empty() && goes_over_nodes(class_of_[slot])) {
       goals_on_nodes_.push_back(goal_on_nodes(slot, given_[slot]++, from));
       on_nodes_.push_back(id);

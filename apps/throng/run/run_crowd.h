@@ -79,7 +79,6 @@ class GoalCrowd {
   std::vector<Place> places_;      // goals of a file
   std::vector<uint64_t> given_;    // goals, by slot
   uint64_t steps_ = 0;
-  std::vector<AvatarState> states_;
   std::vector<Place> goals_;
   std::vector<AvatarId> all_, on_ground_, on_nodes_;
   std::vector<NodePlace> goals_on_nodes_;

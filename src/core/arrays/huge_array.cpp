@@ -25,4 +25,10 @@ ZeroedBytes::ZeroedBytes(size_t bytes, Pages pages) {
 #endif
 }
 
+void ZeroedBytes::give_back(size_t first, size_t bytes) const {
+  constexpr size_t kPage = 4096;
+  const size_t begin = (first + kPage - 1) / kPage * kPage, end = (first + bytes) / kPage * kPage;
+  if (begin < end) madvise(static_cast<uint8_t*>(data_.get()) + begin, end - begin, MADV_DONTNEED);
+}
+
 }  // namespace throng

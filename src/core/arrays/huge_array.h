@@ -28,6 +28,8 @@ class ZeroedBytes {
   ZeroedBytes() = default;
   ZeroedBytes(size_t bytes, Pages pages);
   [[nodiscard]] void* data() const { return data_.get(); }
+  /// Gives the memory of whole pages back, which are zero from then on.
+  void give_back(size_t first, size_t bytes) const;
 
  private:
   std::unique_ptr<void, UnmapPages> data_;
@@ -47,6 +49,10 @@ class HugeArray {
   [[nodiscard]] size_t size() const { return size_; }
   [[nodiscard]] std::span<T> span() const { return {data(), size_}; }
   [[nodiscard]] T& operator[](size_t i) const { return data()[i]; }
+  /// What lies in whole pages of these is zero from now on, and takes no memory.
+  void give_back(size_t first, size_t count) const {
+    bytes_.give_back(first * sizeof(T), count * sizeof(T));
+  }
 
  private:
   ZeroedBytes bytes_;

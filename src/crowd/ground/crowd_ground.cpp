@@ -117,7 +117,7 @@ size_t count_rough(const world::Zone& zone, int32_t avatar_class) {
 }  // namespace
 
 Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t avatar_class,
-                                        int32_t step_mm) {
+                                        int32_t step_mm, const IsNear* is_near) {
   CrowdGround ground;
   ground.tiles_x_ = world.summary.tiles_x;
   ground.tiles_z_ = world.summary.tiles_z;
@@ -142,7 +142,10 @@ Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t a
     if (zone == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
     rough += count_rough(*zone, avatar_class);
   }
-  ground.samples_ = HugeArray<uint16_t>(rough * world::kBlocks * 64);
+  ground.samples_ = HugeArray<uint16_t>(rough * world::kBlocks * 64,
+                                        is_near == nullptr ? Pages::kHuge : Pages::kSmall);
+  ground.sample_slot_.assign(world.level_count, kNoSlot);
+  uint32_t next_slot = 0;
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const world::Zone* zone = world.zone(s);
     const uint32_t base = world.slots[s]->first_level;
@@ -160,7 +163,9 @@ Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t a
       world::LevelView& view = ground.views_[base + i];
       view = level.view;
       if (is_sampled(*zone, i, avatar_class)) {
-        uint16_t* samples = ground.samples_.data() + ground.sample_sets_++ * world::kBlocks * 64;
+        ++ground.sample_sets_;
+        ground.sample_slot_[base + i] = next_slot;
+        uint16_t* samples = ground.samples_of(next_slot++);
         world::unpack_floor(view, samples);
         view.samples = samples;
       }
@@ -200,12 +205,39 @@ Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t a
                         static_cast<size_t>(record.tile_x)];
       if (range.last == 0) range.first = base + i;
       range.last = base + i + 1;
+      if (view.samples != nullptr && is_near != nullptr &&
+          !(*is_near)(record.tile_x, record.tile_z)) {
+        ground.drop_samples(base + i);
+      }
     }
   }
   ground.find_isolated(step_mm);
   ground.find_uneven();
   ground.join_blocks();
   return ground;
+}
+
+void CrowdGround::drop_samples(Level level) {
+  --sample_sets_;
+  views_[level].samples = nullptr;
+  samples_.give_back(size_t{sample_slot_[level]} * 4096, 4096);
+}
+
+void CrowdGround::keep_near(IsNear is_near) {
+  for (Level level = 0; level < sample_slot_.size(); ++level) {
+    const uint32_t slot = sample_slot_[level];
+    if (slot == kNoSlot) continue;
+    world::LevelView& view = views_[level];
+    const bool is_wanted = is_near(records_[level].tile_x, records_[level].tile_z);
+    if (is_wanted == (view.samples != nullptr)) continue;
+    if (!is_wanted) {
+      drop_samples(level);
+      continue;
+    }
+    ++sample_sets_;
+    world::unpack_floor(view, samples_of(slot));
+    view.samples = samples_of(slot);
+  }
 }
 
 void CrowdGround::find_isolated(int32_t step_mm) {

@@ -9,6 +9,7 @@
 
 #include "core/arrays/huge_array.h"
 #include "core/arrays/prefetch.h"
+#include "core/function_ref.h"
 #include "crowd/ground/ground_slope.h"
 #include "crowd/ground/left_cells.h"
 #include "crowd/ground/level_line.h"
@@ -24,10 +25,15 @@ class CrowdGround {
  public:
   using Level = uint32_t;  // of the world
 
-  /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
-  /// world's lowest and highest triangle.
+  /// Is a tile near those on which bodies of this process walk?
+  using IsNear = FunctionRef<bool(int32_t tile_x, int32_t tile_z)>;
+  /// Opens every zone of the world. Heights far from where bodies walk are read from its zones,
+  /// which is slower, and gives the same; null: they walk everywhere. Fails with kBadFile, also
+  /// where floors are not between the world's lowest and highest triangle.
   static Result<CrowdGround> create(const world::WorldData& world, int32_t avatar_class,
-                                    int32_t step_mm);
+                                    int32_t step_mm, const IsNear* is_near = nullptr);
+  /// Bodies walk elsewhere from now on. Not while others read.
+  void keep_near(IsNear is_near);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;
@@ -141,7 +147,7 @@ class CrowdGround {
                            sizeof(LevelLine) + sizeof(OpenLine);
     return records_.size() * level + tiles_.size() * sizeof(Range) +
            row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t) +
-           baked_.size() * sizeof(Baked);
+           baked_.size() * sizeof(Baked) + sample_slot_.size() * sizeof(uint32_t);
   }
   [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
   [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
@@ -171,6 +177,7 @@ class CrowdGround {
   };
   void keep_baked(Level level, Baked& baked);
 
+  void drop_samples(Level level);
   void find_isolated(int32_t step_mm);
   // ground_slope.cpp
   void find_uneven();
@@ -218,7 +225,12 @@ class CrowdGround {
   // Floors that are not flat, row by row: each step of an avatar on one reads five of its cells,
   // and decoding these from the zone's blocks takes a fifth of the step.
   HugeArray<uint16_t> samples_;
-  size_t sample_sets_ = 0;
+  size_t sample_sets_ = 0;             // in use
+  std::vector<uint32_t> sample_slot_;  // by level; kNoSlot: its floor is not stored cell by cell
+  static constexpr uint32_t kNoSlot = UINT32_MAX;
+  [[nodiscard]] uint16_t* samples_of(uint32_t slot) const {
+    return samples_.data() + size_t{slot} * 4096;
+  }
 };
 
 }  // namespace throng::crowd

@@ -55,10 +55,12 @@ void ColumnOwners::find_neighbours() {
   ++version_;
   neighbours_.clear();
   is_at_border_.assign(owners_.size(), false);
+  is_near_.assign(owners_.size(), false);
   for (uint32_t column = 0; column < owners_.size(); ++column) {
     if (owners_[column] != rank_) continue;
     for_columns_around(column, [&](uint32_t other, int32_t, int32_t) {
       const int32_t owner = owners_[other];
+      is_near_[other] = true;
       if (owner == rank_) return;
       is_at_border_[column] = true;
       const auto at = std::lower_bound(neighbours_.begin(), neighbours_.end(), owner);

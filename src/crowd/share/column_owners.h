@@ -38,6 +38,11 @@ class ColumnOwners {
   /// Ranks that own something so near to what this one owns that bodies there may matter to each
   /// other, in order. They have this one among theirs.
   [[nodiscard]] std::span<const int32_t> neighbours() const { return neighbours_; }
+  /// Does this rank own a column within the reach of a tile's?
+  [[nodiscard]] bool is_near(int32_t tile_x, int32_t tile_z) const {
+    const int32_t bits = bits_ - kTileUnitBits;
+    return is_near_[static_cast<size_t>((tile_z >> bits) * wide_ + (tile_x >> bits))];
+  }
   /// Writes which of neighbours() own ground within the reach of a point of a column of this rank,
   /// or of one beside it, in order. [units]
   void find_near(int32_t x, int32_t z, std::vector<uint32_t>& near) const;
@@ -56,6 +61,7 @@ class ColumnOwners {
   uint64_t version_ = 0;
   std::vector<int32_t> owners_;
   std::vector<bool> is_at_border_;  // of columns of this rank
+  std::vector<bool> is_near_;
   std::vector<int32_t> neighbours_;
 };
 

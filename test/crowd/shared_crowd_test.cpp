@@ -171,6 +171,16 @@ TEST(SharedCrowd, WithEveryModelAndInSubSteps) {
   config = {.workers = 1};
   config.routing = Routing::kStraight;
   expect_same(garage(), config, {3}, wanders(garage(), 300, 60), "straight");
+  // Low detail beyond a view, where avatars take four steps at once.
+  config = {.workers = 1};
+  config.tuning.low_detail_steps = 4;
+  const Box3d all = garage().summary().bounds;
+  const CrowdView view{.position = (all.min + all.max) * 0.5, .radius = 8};
+  const auto seen = [&](Crowd& crowd, const Edits& edits, Course& course) {
+    crowd.set_views({&view, 1});
+    wanders(garage(), 300, 60)(crowd, edits, course);
+  };
+  expect_same(garage(), config, {2, 3}, seen, "levels of detail");
 }
 
 // Avatars that come, go, change their speeds, are driven, head to targets and are watched.

@@ -51,13 +51,13 @@ struct Totals {
   double progress = 0;
   uint64_t checks = 0;
   CrowdCheck found;
-  uint64_t ranks = 1, most_avatars = 0, sent_bytes = 0;  // of all steps, by the rank that sent most
+  uint64_t ranks = 1, most_avatars = 0;
+  std::vector<uint64_t> sent_bytes;  // of each step, by the rank that sent most
 
   void add(const CrowdReport& r) {
     ranks = static_cast<uint64_t>(r.ranks);
     most_avatars = r.most_avatars;  // at the end
-    sent_bytes += r.sent_bytes;
-    sum.step = r.step;
+    if (r.ranks > 1) sent_bytes.push_back(r.sent_bytes);
     sum.stood += r.stood;
     sum.contested += r.contested;
     sum.arrived += r.arrived;
@@ -78,12 +78,18 @@ struct Totals {
   }
 };
 
+// The first step is not like the others: it shows neighbours all that they see.
+uint64_t median_of(std::vector<uint64_t> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 std::string rank_text(const Totals& t) {
   if (t.ranks <= 1) return {};
   return fmt::format("{} ranks, at most {} avatars on one; {:.1f} kB sent by one in a step\n",
-                     t.ranks, t.most_avatars,
-                     static_cast<double>(t.sent_bytes) * 1e-3 /
-                         std::max<double>(1, static_cast<double>(t.sum.step)));
+                     t.ranks, t.most_avatars, static_cast<double>(median_of(t.sent_bytes)) * 1e-3);
 }
 
 // What all ranks know; rank 0 prints it.
@@ -131,7 +137,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
   if (t.ranks > 1) {
     json["ranks"] = t.ranks;
     json["most_avatars"] = t.most_avatars;
-    json["sent_bytes"] = static_cast<double>(t.sent_bytes) / steps;
+    json["sent_bytes"] = median_of(t.sent_bytes);
   }
   const uint64_t hash = crowd.state_hash();
   json["state_hash"] = fmt::format("{:016x}", hash);

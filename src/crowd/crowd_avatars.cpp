@@ -237,7 +237,7 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   constexpr size_t kWhile = 4096;
   std::vector<crowd::NewAvatar> draws;
   std::vector<uint8_t> is_there, blocked;
-  uint64_t failed = 0, drawn = 0;
+  size_t failed = 0, drawn = 0;
   while (is_own.size() < count && *has_places) {
     // One by one; but ranks ask each other for many at once.
     const size_t many =

@@ -8,18 +8,16 @@ import json
 import os
 import pathlib
 import random
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
+from mpi_processes import ENVIRONMENT, MPIRUN, ours, ranks_of
+
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 TRIALS = pathlib.Path(__file__).resolve().parents[2] / "trials"
-MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
-ENVIRONMENT = {**os.environ, "OMPI_MCA_mpi_yield_when_idle": "1",
-               **({} if shutil.which("ssh") else {"OMPI_MCA_plm_rsh_agent": "/bin/false"})}
 # Of a run by several processes: what differs, and what only they say.
 OWN = ("threads", "crowd_bytes", "peak_bytes", "ranks", "most_avatars", "sent_bytes")
 
@@ -74,21 +72,6 @@ def test_scenarios(folder, whole):
         assert trips[0].read_bytes() == trips[1].read_bytes(), file
 
 
-def ranks_of(launcher):
-    """The processes that a running mpirun has started, by rank."""
-    found = {}
-    for entry in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            parent = (entry / "stat").read_text().rpartition(")")[2].split()[1]
-            names = (entry / "environ").read_bytes().split(b"\0")
-        except OSError:
-            continue
-        for name in names:
-            if int(parent) == launcher and name.startswith(b"OMPI_COMM_WORLD_RANK="):
-                found[int(name.partition(b"=")[2])] = int(entry.name)
-    return found
-
-
 def kill_and_resume(folder, words, one, seed):
     """A rank dies at a random moment; the run goes on with another number of ranks. True if it was killed amid steps."""
     chance = random.Random(seed)
@@ -106,7 +89,7 @@ def kill_and_resume(folder, words, one, seed):
     if process.returncode == 0:  # It was done before.
         assert json.loads(out)["state_hash"] == one["state_hash"], out
         return False
-    lines = {line for line in err.splitlines() if line.startswith("throng: ")}
+    lines = set(ours(err))
     assert lines and all("ended in step" in line and f"--resume {file}" in line for line in lines), err
     again, _ = said(run(chance.choice((1, 2, 4)), *words, "--resume", file))
     for key in ("state_hash", "steps", "overlaps", "wall_entries"):
@@ -135,7 +118,7 @@ def test_checkpoints(folder, kills):
         (folder / "broken").write_bytes(broken)
         done = run(1, *words, "--resume", folder / "broken")
         assert done.returncode == 2 and "broken" in done.stderr + "crowd: broken", (broken[:40], done.stderr)
-        assert len([line for line in done.stderr.splitlines() if line.startswith("throng: ")]) == 1, done.stderr
+        assert len(ours(done.stderr)) == 1, done.stderr
     return killed
 
 
@@ -145,7 +128,7 @@ def test_refusals(folder):
 
     def refused(*words):
         done = run(2, "run", world, "--avatars", 20, "--steps", 5, *words)
-        lines = [line for line in done.stderr.splitlines() if line.startswith("throng: ")]
+        lines = ours(done.stderr)
         assert done.returncode == 2 and not done.stdout.strip() and len(lines) == 1, done.stdout + done.stderr
         return lines[0]
 

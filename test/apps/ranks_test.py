@@ -15,15 +15,11 @@ import sys
 import tempfile
 import time
 
+from mpi_processes import ENVIRONMENT, MPIRUN, ours, ranks_of
+
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 MODEL = "builtin:city,size=300,seed=3"
 OPTIONS = ["--zone", "25.6", "--json"]
-MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else [])]
-# A busy machine may need more than the second that Open MPI leaves between its two signals. One without ssh has no
-# other machines to start ranks on, and Open MPI must not look for one.
-# Ranks that wait give their core away: there are more of them than cores.
-ENVIRONMENT = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "3", "OMPI_MCA_mpi_yield_when_idle": "1",
-               **({} if shutil.which("ssh") else {"OMPI_MCA_plm_rsh_agent": "/bin/false"})}
 SESSIONS = tempfile.TemporaryDirectory()  # of Open MPI: two that start at once may not share a folder
 RECORD = 48  # bytes of the journal for each zone
 
@@ -40,25 +36,8 @@ def run(words):
     return subprocess.run(words, capture_output=True, text=True, check=False, env=environment())
 
 
-def ours(text):
-    return [line for line in text.splitlines() if line.startswith("throng: ")]
-
-
 def content(world):
     return {str(file.relative_to(world)): file.read_bytes() for file in world.rglob("*") if file.is_file()}
-
-
-def child_of_rank(parent, rank):
-    """The process of a rank that mpirun has started, or None."""
-    for folder in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            stat = (folder / "stat").read_text().rpartition(")")[2].split()
-            names = (folder / "environ").read_bytes().split(b"\0")
-        except OSError:
-            continue
-        if int(stat[1]) == parent and f"OMPI_COMM_WORLD_RANK={rank}".encode() in names:
-            return int(folder.name)
-    return None
 
 
 def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=(), model=MODEL):
@@ -73,7 +52,7 @@ def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=(), model=MODE
         while process.poll() is None:
             if journal.exists() and journal.stat().st_size >= 5 * RECORD and \
                     len(list(part.glob(f"*.{kind}"))) >= files:
-                killed, first = child_of_rank(process.pid, rank), child_of_rank(process.pid, 0)
+                killed, first = ranks_of(process.pid).get(rank), ranks_of(process.pid).get(0)
                 os.kill(killed, signal.SIGKILL)
                 if files and rank != 0:
                     os.kill(first, signal.SIGTERM)
@@ -176,7 +155,7 @@ def kill_amid_nodes(world, rank, ranks, options):
         killed = False
         while process.poll() is None:
             if not killed and len(list(part.glob("*.thn"))) > 3:
-                victim = child_of_rank(process.pid, rank)
+                victim = ranks_of(process.pid).get(rank)
                 if victim is not None:
                     os.kill(victim, signal.SIGKILL)
                     killed = True

@@ -481,9 +481,9 @@ int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes&
     show_progress(session, "walk", step, run.steps);
     if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
   }
-  last_words({});
   if (auto ok = times.measure("write", finished); !ok) return fail(ok.error());
   print(session, run, crowd.crowd(), totals, times);
+  last_words({});
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
 }
 

@@ -161,7 +161,9 @@ int run_program(int argc, const char* const* argv,
 }
 
 void last_words(const std::string& sentence) {
-  static std::string kept[2];  // the one that a signal may just be writing, and the next
+  // The one that a signal may just be writing, and the next. They outlive what ends at exit, where
+  // ranks wait for each other once more.
+  static auto* const kept = new std::string[2];
   static int next = 0;
   if (sentence.empty() || rank_info().rank > 1) {  // As fail() does.
     g_last_words = sentence.empty() ? nullptr : "";

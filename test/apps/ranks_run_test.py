@@ -81,12 +81,12 @@ def kill_and_resume(folder, words, one, seed):
         deadline = time.monotonic() + 60
         while not file.exists() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.01)
-        time.sleep(chance.uniform(0, 0.5))
+        time.sleep(chance.uniform(0, 0.8))
         victim = ranks_of(process.pid).get(chance.randrange(ranks))
         if victim is not None and process.poll() is None:
             os.kill(victim, signal.SIGKILL)
         out, err = process.communicate(timeout=120)
-    if process.returncode == 0:  # It was done before.
+    if out.strip():  # It was done before: rank 0 has printed.
         assert json.loads(out)["state_hash"] == one["state_hash"], out
         return False
     lines = set(ours(err))
@@ -100,7 +100,7 @@ def kill_and_resume(folder, words, one, seed):
 def test_checkpoints(folder, kills):
     world = folder / "city.throng"
     assert run(1, "bake", "builtin:city,size=120,seed=3", "-o", world).returncode == 0
-    words = ["run", world, "--avatars", 300, "--steps", 150, "--near", 30, "--threads", 1, "--json"]
+    words = ["run", world, "--avatars", 300, "--steps", 400, "--near", 30, "--threads", 1, "--json"]
     one, _ = said(run(1, *words))
     killed = sum(kill_and_resume(folder, words, one, seed) for seed in range(1, kills + 1))
     assert killed >= kills / 2, f"only {killed} of {kills} were killed amid steps"

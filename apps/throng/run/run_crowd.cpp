@@ -158,7 +158,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
           rank_text(t));
 }
 
-// If another rank dies, this one is ended while it waits for it.
+// If another rank dies, this one is ended while it waits for it: in a step, or at its end.
 void set_last_words(const CrowdRun& run, uint64_t step, std::optional<uint64_t> saved_at) {
   if (rank_info().size <= 1) return;
   const std::string& file =
@@ -483,7 +483,6 @@ int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes&
   }
   if (auto ok = times.measure("write", finished); !ok) return fail(ok.error());
   print(session, run, crowd.crowd(), totals, times);
-  last_words({});
   return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
 }
 

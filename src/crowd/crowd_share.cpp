@@ -10,6 +10,7 @@
 #include "core/access.h"
 #include "core/arrays/release.h"
 #include "crowd/crowd_state.h"
+#include "crowd/mode/saved_rows.h"
 #include "crowd/shared_crowd.h"
 #include "crowd/standing_map.h"
 
@@ -212,9 +213,9 @@ void Crowd::State::gather_events(crowd::EngineCounts& counts, CrowdReport& repor
                   {size_of(shared.arrived), size_of(shared.goal_unreachable), size_of(no_progress),
                    size_of(entered)}};
   std::vector<uint8_t> bytes;
-  put_value(bytes, mine);
+  crowd::put_rows(bytes, &mine, 1);
   for_events([&](auto& events) {
-    for (const auto& event : events) put_value(bytes, event);
+    crowd::put_rows(bytes, events.data(), events.size());
     events.clear();
   });
   counts = {};

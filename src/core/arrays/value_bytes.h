@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -11,14 +10,6 @@
 
 /// Values as the bytes of messages between ranks, which run the same program.
 namespace throng {
-
-template <class T>
-void put_value(std::vector<uint8_t>& bytes, const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  const size_t begin = bytes.size();
-  bytes.resize(begin + sizeof value);
-  std::memcpy(bytes.data() + begin, &value, sizeof value);
-}
 
 /// As many values as the bytes hold.
 template <class T>
